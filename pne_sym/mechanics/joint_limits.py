@@ -78,7 +78,7 @@ def _limits(book: Book, g: LegGeometry, j: int) -> tuple[Any, ...]:
     unit = g.kind(j).unit
     symbols = book.parameters.add(
         ParameterField(
-            f"{legs.name}_joint{j}_limits",
+            f"{legs.name}_{legs.part('joint', j)}_limits",
             legs.name,
             (2,),
             unit,

@@ -99,11 +99,11 @@ S_ddot_b   | \ddot{\mathbf S}_b       | MOVING_FRAME | beyond the paper
     acceleration of the connection point in space, less that of the base origin
 a_b0       | \mathbf a_{b0}           | MOVING_FRAME | beyond the paper
     acceleration of the base point, less that of the base origin
-omega_b#   | \boldsymbol\omega_{b#}   | MOVING_FRAME | beyond the paper
+omega_b_#  | \boldsymbol\omega_{b#}   | MOVING_FRAME | beyond the paper
     angular velocity of link # in space
-W_b#       | \mathbf W_{b#}           | DEFINITION symmetric
+W_b_#      | \mathbf W_{b#}           | DEFINITION symmetric
     centripetal tensor of link # in space
-zeta_b#    | \boldsymbol\zeta_{b#}    | MOVING_FRAME | beyond the paper
+zeta_b_#   | \boldsymbol\zeta_{b#}    | MOVING_FRAME | beyond the paper
     angular acceleration of link # from the turning of its axis in space
 beta_#     | \boldsymbol\beta_{#}     | RATE
     angular acceleration of link # at zero joint accelerations
@@ -604,10 +604,10 @@ class MotionWriter:
         for j in self.spans:
             if j:
                 previous, frame = omega[g.group[j - 1]], g.frame("axes", j)
-                omega[j] = self.eq("omega_b#", previous + motion.qd[j] * g.spin(j), j, body=frame)
-                spin[j] = self.eq("W_b#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
+                omega[j] = self.eq("omega_b_#", previous + motion.qd[j] * g.spin(j), j, body=frame)
+                spin[j] = self.eq("W_b_#", Compose(Skew(omega[j]), Skew(omega[j])), j, body=frame)
                 turn = motion.qd[j] * Cross(previous, g.spin(j))
-                turned[j] = self.eq.named("zeta_b#", turn, j, body=frame)
+                turned[j] = self.eq.named("zeta_b_#", turn, j, body=frame)
         return replace(
             motion,
             omega=omega,

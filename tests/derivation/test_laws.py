@@ -49,8 +49,8 @@ LIMIT        | beyond the paper      | margin_# off_# off#_#
 LUMPING      |                       | half_# legs_size m_star middle_# per_turn_# rho_tip_# size
 LUMPING      |                       | size_# spread vs#_end_p
 LUMPING      |                       | trace_J_# trace_J_group_# un_# um_# uu_# vs#_# end_l#
-MOVING_FRAME | beyond the paper      | B_b S_ddot_b a_b# a_m f_b g_b g_f mu_b omega_b# zeta_b#
-DEFINITION   |                       | W_b#
+MOVING_FRAME | beyond the paper      | B_b S_ddot_b a_b# a_m f_b g_b g_f mu_b omega_b_# zeta_b_#
+DEFINITION   |                       | W_b_#
 NEWTON       |                       | P_c_# T_#
 NEWTON       | Eq. 1                 | f_# phi_#
 NEWTON       | Eq. 3                 | c_true
