@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_functions import LANES, function_text
+from pne_sym.backends.c_functions import LANES, FunctionText, function_text
 from pne_sym.backends.c_model import (
     default_values,
     model_fields,
@@ -14,7 +14,8 @@ from pne_sym.backends.c_model import (
     prepare_body,
 )
 from pne_sym.backends.c_public import Caller, c_functions
-from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest
+from pne_sym.backends.c_solve import Order
+from pne_sym.backends.c_steps import OPERATIONS, Steps, biggest, results_of, runs_in_lanes
 from pne_sym.backends.c_support import needed
 from pne_sym.backends.c_text import Routine, wrapped
 from pne_sym.backends.describe import Described, describe
@@ -88,25 +89,25 @@ class CBackend:
 
 def _view(bundle: Bundle) -> CView:
     """What the templates print."""
-    functions, runs = _functions(bundle)
+    functions = _functions(bundle)
     closures = tuple(
         CClosure(
             closure,
             bundle.program.shapes[f"gap_{(leg := closure.leg_type)}"][1],
-            runs[closure.function].call_with(
-                {"w": "1", "joints": "q", f"gap_{leg}": "gap", f"jacobian_{leg}": "jacobian"}
+            functions[closure.function].one.call_with(
+                {"joints": "q", f"gap_{leg}": "gap", f"jacobian_{leg}": "jacobian"}
             ),
         )
         for closure in bundle.program.closures
     )
-    steps, routines = _steps(bundle, runs)
-    users = [Caller(bundle.name, f, routines[f.of.name]) for f in c_functions(bundle)]
+    steps, routines = _steps(bundle, functions)
+    users = [Caller(bundle.name, f, *routines[f.of.name]) for f in c_functions(bundle)]
     closing = {closure.function for closure in bundle.program.closures}
     texts = [
-        *(t for n, t in functions.items() if n in closing),
+        *(f.text for n, f in functions.items() if n in closing),
         *([_closing(bundle, closures)] if closures else []),
         "/* ---- functions of the state: M, Z, H and the like ---- */",
-        *(t for n, t in functions.items() if n not in closing),
+        *(f.text for n, f in functions.items() if n not in closing),
         "/* ---- what users call, as steps over these ---- */",
         *steps,
         "/* ---- one state, and batches ---- */",
@@ -168,23 +169,36 @@ def _closing(bundle: Bundle, closures: tuple[CClosure, ...]) -> str:
     )
 
 
-def _functions(bundle: Bundle) -> tuple[dict[str, str], dict[str, Routine]]:
-    """Texts of the program's functions that are run, and the routines that run them."""
-    texts, runs, program = {}, {}, bundle.program
+def _functions(bundle: Bundle) -> dict[str, FunctionText]:
+    """The program's functions that are run; for states side by side where a public one wants it."""
+    program = bundle.program
     run = {name for f in program.public for name in f.functions}
     run |= {closure.function for closure in program.closures}
-    for function in (f for n, f in program.functions.items() if n in run):
-        texts[function.name], runs[function.name] = function_text(bundle, function)
-    return texts, runs
+    lanes = {name for f in program.public if runs_in_lanes(f) for name in f.functions}
+    summed = {name for f in program.public for name in results_of(f).values()}
+    return {
+        name: function_text(bundle, function, lanes=name in lanes, summed=name in summed)
+        for name, function in program.functions.items()
+        if name in run
+    }
 
 
-def _steps(bundle: Bundle, runs: dict[str, Routine]) -> tuple[list[str], dict[str, Routine]]:
-    """Texts of the public functions' steps, and the routines that run them."""
+def _steps(
+    bundle: Bundle, functions: dict[str, FunctionText]
+) -> tuple[list[str], dict[str, tuple[Routine, Routine | None]]]:
+    """Texts of the public functions' steps, and the routines that run them: one state, lanes."""
     texts: list[str] = []
-    routines: dict[str, Routine] = {}
+    routines: dict[str, tuple[Routine, Routine | None]] = {}
+    eliminations: dict[Order, Routine] = {}
     for function in bundle.program.public:
-        if any(o.value.size for o in function.outputs):
-            steps = Steps(bundle, function, runs, routines)
-            routines[function.name] = steps.routine()
-            texts += [*steps.before, "\n".join(routines[function.name].definition())]
+        if not any(o.value.size for o in function.outputs):
+            continue
+        found = []
+        for lanes in [False, True] if runs_in_lanes(function) else [False]:
+            runs = {n: functions[n].run(lanes=lanes) for n in function.functions}
+            parts = {name: one for name, (one, _) in routines.items()}
+            steps = Steps(bundle, function, runs, parts, eliminations, lanes=lanes)
+            found.append(steps.routine())
+            texts += [*steps.before, "\n".join(found[-1].definition())]
+        routines[function.name] = (found[0], found[1] if len(found) > 1 else None)
     return texts, routines

@@ -1,131 +1,167 @@
-"""C code of the program's functions: structures, parts, and what runs the parts."""
+"""C code of the program's functions: parts, and what runs the parts."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import prod
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import Parts, vector_name
-from pne_sym.backends.c_text import Routine, comment, indented, listing
+from pne_sym.backends.c_text import Routine, comment, listing
 from pne_sym.program.count import count_function
 from pne_sym.program.ir import Block, Function
 
 LANES = 8
 
 
-def function_text(bundle: Bundle, function: Function) -> tuple[str, Routine]:
-    """The text of a function of the program, and the routine that runs it."""
-    return _FunctionWriter(bundle, function).text()
+@dataclass(frozen=True)
+class FunctionText:
+    """A function of the program in C.
+
+    Attributes:
+        text: of its parts and of what runs them.
+        one: runs it for one state, the legs side by side.
+        lanes: for as many states as there are lanes, side by side; None where none wants it.
+    """
+
+    text: str
+    one: Routine
+    lanes: Routine | None
+
+    def run(self, *, lanes: bool) -> Routine:
+        """The routine for one state, or for the lanes."""
+        routine = self.lanes if lanes else self.one
+        assert routine is not None
+        return routine
+
+
+def function_text(bundle: Bundle, function: Function, *, lanes: bool, summed: bool) -> FunctionText:
+    """A function of the program.
+
+    Args:
+        bundle: of the model.
+        function: the function.
+        lanes: for states side by side too.
+        summed: with the sum of all that it gives, to tell whether that is finite.
+    """
+    return _FunctionWriter(bundle, function, summed=summed).text(lanes=lanes)
 
 
 class _FunctionWriter:
-    def __init__(self, bundle: Bundle, function: Function) -> None:
+    def __init__(self, bundle: Bundle, function: Function, *, summed: bool) -> None:
         self.bundle = bundle
         self.f = function
         self.name = function.name
-        self.parts = Parts(bundle, function)
+        self.parts = Parts(bundle, function, summed=summed)
         self.before = self.parts.before()
         self.legs = [(b, self.parts.over(b), self.parts.place(b)) for b in self.parts.legs]
         self.after = self.parts.after() if self.parts.last else None
 
-    def text(self) -> tuple[str, Routine]:
+    def text(self, *, lanes: bool) -> FunctionText:
         """All routines, each after what it calls."""
         n = count_function(self.f, self.bundle.leg_counts)
         lines = comment(
             f"---- {self.name}: {n.mul} mul, {n.add} add, {n.div} div, {n.sqrt} sqrt, "
             f"{n.trig} trig, every leg counted ----"
         )
-        lines += [*self._structures(), "", *self.before.definition(), ""]
+        lines += [*self.before.definition(), ""]
         for _, over, place in self.legs:
             lines += [*over.definition(), "", *place.definition(), ""]
         if self.after:
             lines += [*self.after.definition(), ""]
-        run = self._run()
-        return "\n".join([*lines, *run.definition()]), run
-
-    def _structures(self) -> list[str]:
-        """What passes from part to part, and what the legs give."""
-        fields = [f"{n}[LANES]" for n in self.parts.passed_fields()]
-        if self.parts.sums:
-            fields.append(f"sum[{len(self.parts.sums)}][LANES]")
-        lines = _structure(f"{self.name}_values", fields or ["none[1]"])
-        for block in self.parts.legs:
-            width = max(LANES, self.bundle.leg_counts[block.leg_type])
-            lines += _structure(
-                f"{self.name}_results_{block.leg_type}", self.parts.results(block, width)
-            )
-        return lines
+        one, many = self._run("1"), self._run("LANES") if lanes else None
+        lines += one.definition()
+        lines += ["", *many.definition()] if many else []
+        return FunctionText("\n".join(lines), one, many)
 
     # ---- what runs the parts -------------------------------------------------------------
 
-    def _run(self) -> Routine:
+    def _run(self, w: str) -> Routine:
         """The parts one after another, for one state or for as many as there are lanes."""
+        single = w == "1"
         body = [
-            f"clear({a}, {prod(self.bundle.program.shapes[a])}*w);"
+            f"clear({a}, {_times(prod(self.bundle.program.shapes[a]), w)});"
             for a in self.f.arrays
             if not self.parts.is_full(a)
         ]
-        body.append(self.before.call())
+        body.append(self.before.call_with({"w": w}))
         for block, over, place in self.legs:
-            body += self._run_legs(block, over, place)
+            body += (self._side_by_side if single else self._in_turn)(block, over, place)
         if self.after:
-            body.append(self.after.call())
-        head = [f"{self.name}_results_{b.leg_type} results_{b.leg_type};" for b in self.parts.legs]
+            body.append(self.after.call_with({"w": w}))
+        words = "\n".join(body)
+        sizes = {"s": len(self.parts.passed), "sums": len(self.parts.sums)}
+        names = [n for n, k in sizes.items() if k and f" {n}" in words]
+        buffers = [f"{n}[{_times(sizes[n], w)}]{' = {0}' * single}" for n in names]
+        for block in self.parts.legs:
+            width = f"LEGS({self.bundle.leg_counts[block.leg_type]})" if single else w
+            rows = len(block.stores) + len(self.parts.flag_rows(block))
+            terms = len(block.sums) if single else 0
+            sizes = {f"terms_{block.leg_type}": terms, f"o_{block.leg_type}": rows}
+            # gcc's analyzer does not see that the legs set all of it
+            zero = " = {0}" * single
+            buffers += [f"{n}[{k}*{width}]{zero}" for n, k in sizes.items() if k]
         parameters = [
             "const prepared *m",
-            "size_t w",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
-        routine = Routine.of(f"{self.name}_run", parameters, [*head, *body])
-        if any(p.endswith(" *s") for r in (self.before, self.after) if r for p in r.parameters):
-            head.insert(0, f"{self.name}_values values, *const s = &values;")
-        return Routine(routine.name, routine.parameters, (*head, *body))
+        head = listing("real ", buffers, ";") if buffers else []
+        return Routine.of(
+            f"{self.name}_run{'' if single else '_lanes'}", parameters, [*head, *body]
+        )
 
-    def _run_legs(self, block: Block, over: Routine, place: Routine) -> list[str]:
-        count = self.bundle.leg_counts[block.leg_type]
-        results = {"o": f"&results_{block.leg_type}"}
-        each = f"for (size_t leg = 0; leg < {count}; ++leg) {{"
-        legs = {"leg": "0", "legs": "1", "states": "0", "count": str(count), "add": "0"}
-        states = {"legs": "0", "states": "1", "count": "w", "add": "1"}
-        return [
-            "if (w == 1) {  /* the legs side by side */",
-            *indented(self._clear_sums(block) if len(block.sums) == 1 else []),
-            f"    {over.call_with(results | legs)}",
-            f"    {each}",
-            f"        {place.call_with({**results, 'first': 'leg'})}",
-            "    }",
-            *indented(self._sums(block, f"total({{}}, {count})", states="1")),
-            "} else {  /* the states side by side */",
-            *indented(self._clear_sums(block)),
-            f"    {each}",
-            f"        {over.call_with(results | states)}",
-            f"        {place.call_with({**results, 'first': '0'})}",
-            "    }",
-            *indented(self._sums(block, "{}[k]", states="w")),
-            "}",
-        ]
-
-    def _clear_sums(self, block: Block) -> list[str]:
-        """Zeros; a single sum has them for one state too, where gcc's analyzer misses the legs'."""
-        sums = f"results_{block.leg_type}.sum"
-        return [f"memset({sums}, 0, sizeof {sums});"] if block.sums else []
-
-    def _sums(self, block: Block, source: str, states: str) -> list[str]:
-        """Sums over the legs, put where the last part finds them."""
+    def _side_by_side(self, block: Block, over: Routine, place: Routine) -> list[str]:
+        """The legs of one state, side by side."""
+        legs = self.bundle.leg_counts[block.leg_type]
+        given = {"w": "1", "count": f"LEGS({legs})", **self._arrays(block, single=True)}
+        at = {"leg": "0", "legs": "1", "states": "0", "add": "0"}
+        lines = [over.call_with(given | at)]
+        if place.body:
+            lines += [
+                f"for (size_t leg = 0; leg < {legs}; ++leg) {{",
+                f"    {place.call_with({**given, 'first': 'leg'})}",
+                "}",
+            ]
         if not block.sums:
-            return []
-        first = self.parts.sums.index(str(block.sums[0][0]))
-        target = f"s->sum[{first} + n][k]" if first else "s->sum[n][k]"
+            return lines
+        terms = f"terms_{block.leg_type}"
         return [
+            *lines,
             f"for (size_t n = 0; n < {len(block.sums)}; ++n) {{",
-            f"    for (size_t k = 0; k < {states}; ++k) {{",
-            f"        {target} = {source.format(f'results_{block.leg_type}.sum[n]')};",
-            "    }",
+            f"    sums[{self._first(block)}n] = total({terms} + n*LEGS({legs}), {legs});",
             "}",
         ]
 
+    def _in_turn(self, block: Block, over: Routine, place: Routine) -> list[str]:
+        """One leg after another, the states side by side."""
+        legs = self.bundle.leg_counts[block.leg_type]
+        given = {"w": "LANES", "count": "LANES", **self._arrays(block, single=False)}
+        at = {"legs": "0", "states": "1", "add": "1"}
+        sums = f"clear({given['terms']}, {len(block.sums)}*LANES);"
+        return [
+            *([sums] if block.sums else []),
+            f"for (size_t leg = 0; leg < {legs}; ++leg) {{",
+            f"    {over.call_with(given | at)}",
+            *([f"    {place.call_with({**given, 'first': '0'})}"] if place.body else []),
+            "}",
+        ]
 
-def _structure(name: str, fields: list[str]) -> list[str]:
-    return ["typedef struct {", *indented(listing("real ", fields, ";")), f"}} {name};"]
+    def _first(self, block: Block) -> str:
+        """Place of the first sum of a block."""
+        first = self.parts.sums.index(str(block.sums[0][0])) if block.sums else 0
+        return f"{first} + " if first else ""
+
+    def _arrays(self, block: Block, *, single: bool) -> dict[str, str]:
+        """Arrays of what the legs give; states side by side are added up in place."""
+        at = self._first(block).replace(" + ", "*LANES")
+        sums = f"sums + {at}" if at else "sums"
+        return {
+            "terms": f"terms_{block.leg_type}" if single else sums,
+            "o": f"o_{block.leg_type}",
+        }
+
+
+def _times(n: int, w: str) -> str:
+    return str(n) if w == "1" else f"{n}*{w}"

@@ -5,8 +5,16 @@ from __future__ import annotations
 import math
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_parts import statements
-from pne_sym.backends.c_text import PRINTER, c_name, comment, indented, listing, statement
+from pne_sym.backends.c_parts import capacity, statements
+from pne_sym.backends.c_text import (
+    PRINTER,
+    c_name,
+    comment,
+    indented,
+    listing,
+    statement,
+    words_of,
+)
 from pne_sym.backends.describe import equation_titles, field_views
 from pne_sym.derivation import ParameterField, Rule
 from pne_sym.program.ir import Block
@@ -45,14 +53,20 @@ def _literal(row: str) -> str:
 
 
 def model_fields(bundle: Bundle) -> list[str]:
-    """Members of the prepared model: shared values, then arrays over the legs of a type."""
+    """Members of the prepared model: arrays over the legs of a type, then shared values.
+
+    The arrays come first, so that vectors in them lie as evenly in memory as the model does.
+    """
     real, program = f"{bundle.name}_real", bundle.program
-    shared = [c_name(n) for n, leg in program.prepared if not leg]
-    lines = listing(f"{real} ", shared, ";", "        ") if shared else []
+    lines = []
     for leg, count in bundle.leg_counts.items():
-        own = [f"{c_name(n)}[{count}]" for n, of in program.prepared if of == leg]
+        own = [f"{c_name(n)}[{capacity(count)}]" for n, of in program.prepared if of == leg]
+        copies = "; copies of the first fill up" * (capacity(count) > count)
         if own:
-            lines += [*comment(f"legs of type {leg}"), *listing(f"{real} ", own, ";", "        ")]
+            lines += comment(f"{count} legs of type {leg}{copies}")
+            lines += listing(f"{real} ", own, ";", "        ")
+    shared = [c_name(n) for n, leg in program.prepared if not leg]
+    lines += listing(f"{real} ", shared, ";", "        ") if shared else []
     return lines or [f"{real} none;"]
 
 
@@ -89,10 +103,17 @@ class _Preparation:
         inner += statements(block.assignments, self.titles, self.printer)
         for store in block.stores:
             inner.append(f"model->{c_name(store.array)}[leg] = {self.printer.text(store.value)};")
-        for target, value in block.sums:
-            inner += statement(f"{c_name(str(target))} += {self.printer.text(value)}")
         count = self.bundle.leg_counts[leg]
-        return [f"for (size_t leg = 0; leg < {count}; ++leg) {{", *indented(inner), "}"]
+        filled = capacity(count) > count
+        for target, value in block.sums:
+            term = self.printer.text(value)
+            inner += statement(
+                f"{c_name(str(target))} += {f'leg < {count} ? {term} : 0' if filled else term}"
+            )
+        if "own" in words_of(inner):
+            own = f"leg < {count} ? leg : 0" if filled else "leg"
+            inner.insert(0, f"const size_t own = {own};")
+        return [f"for (size_t leg = 0; leg < {capacity(count)}; ++leg) {{", *indented(inner), "}"]
 
     def _parameters(self, used: set[str], leg: str | None) -> list[str]:
         """The entries of the parameters, and the signs of the branches, that are used."""
@@ -104,13 +125,13 @@ class _Preparation:
             if name in used and leg_type == leg:
                 values = ", ".join(map(str, signs))
                 lines.append(f"static const signed char signs_{name}[] = {{{values}}};")
-                lines.append(f"const real {c_name(name)} = signs_{name}[leg];")
+                lines.append(f"const real {c_name(name)} = signs_{name}[own];")
         return lines
 
 
 def _entry(parameter: ParameterField, index: int) -> str:
     """Where an entry of a parameter stands."""
-    at = parameter.name + ("[leg]" if parameter.leg_type else "")
+    at = parameter.name + ("[own]" if parameter.leg_type else "")
     if parameter.shape == (3, 3):
         return f"{at}[{index // 3}][{index % 3}]"
     return f"{at}[{index}]" if parameter.shape else at

@@ -2,12 +2,16 @@
 
 Every part is written once.  Before and after the legs it is a loop over `w` states that stand
 side by side; over the legs it is a loop over items: the legs of one state, or one leg of
-several states.
+several states.  Arrays have their items side by side: what passes from part to part, s[n*w + k];
+the sums over the legs, sums[n*w + k]; what a leg gives, terms[n*count + k] and o[n*count + k].
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
+
+import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_text import (
@@ -17,6 +21,7 @@ from pne_sym.backends.c_text import (
     Routine,
     c_name,
     comment,
+    in_pairs,
     indented,
     statement,
     table,
@@ -29,6 +34,7 @@ from pne_sym.program.slices import columns, flat_places, is_full, slices, symbol
 
 _SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
 _TROUBLES = ("unreachable", "singular")
+_WORTH = 3
 
 
 def vector_name(vector: str) -> str:
@@ -37,9 +43,19 @@ def vector_name(vector: str) -> str:
 
 
 def statements(
-    assignments: Iterable[Assignment], titles: dict[str, str], printer: CPrinter
+    assignments: Iterable[Assignment],
+    titles: dict[str, str],
+    printer: CPrinter,
+    loads: dict[str, str] | None = None,
 ) -> list[str]:
-    """Assignments, headed by the equations they belong to."""
+    """Assignments, headed by the equations they belong to; what they read is loaded before them.
+
+    Args:
+        assignments: in order.
+        titles: of the equations.
+        printer: of expressions.
+        loads: where the names stand that are not yet at hand; those that are read are taken out.
+    """
     lines: list[str] = []
     equation = ""
     for a in assignments:
@@ -47,16 +63,24 @@ def statements(
             equation = a.equation
             title = titles.get(equation, "")
             lines += comment(f"({equation}) {title}" if title else f"{equation}: named entries")
+        lines += loaded(loads or {}, a.expr)
         lines += statement(f"const real {c_name(str(a.target))} = {printer.text(a.expr)}")
     return lines
 
 
-class Parts:
-    """The parts of one function, as routines."""
+def loaded(loads: dict[str, str], *expressions: Any) -> list[str]:
+    """Loads of what expressions read and is not yet at hand."""
+    names = sorted({s.name for e in expressions for s in sp.sympify(e).free_symbols} & set(loads))
+    return [f"const real {c_name(n)} = {loads.pop(n)};" for n in names]
 
-    def __init__(self, bundle: Bundle, function: Function) -> None:
+
+class Parts:
+    """The parts of one function, as routines; `summed`: with the sum of all that it gives."""
+
+    def __init__(self, bundle: Bundle, function: Function, *, summed: bool) -> None:
         self.bundle = bundle
         self.f = function
+        self.summed = summed
         self.name = function.name
         self.printer = PRINTER
         self.titles = equation_titles(bundle.derivation)
@@ -68,10 +92,6 @@ class Parts:
         )
         self.passed, self.sums = self.slices.passed, self.slices.sums
         self.made = self.slices.made
-
-    def passed_fields(self) -> list[str]:
-        """Names of what the later parts need."""
-        return [c_name(n) for n in self.passed]
 
     def columns(self, array: str) -> int:
         """Length of a row of an output array."""
@@ -85,122 +105,115 @@ class Parts:
 
     def before(self) -> Routine:
         """Names the inputs, computes what the legs share."""
-        reads = self.slices.reads_before
-        lines = []
-        for vector in self.f.inputs:
-            size = self.bundle.coordinates.sizes[_SIZES[vector]]
-            lines += [
-                f"const real {vector}_{e} = {vector_name(vector)}[{e}*w + k];"
-                for e in range(size)
-                if f"{vector}_{e}" in reads
-            ]
-        lines += self._prepared(self.f.shared, reads)
-        lines += statements(self.f.unpack, self.titles, self.printer)
+        loads = {
+            f"{vector}_{e}": f"{vector_name(vector)}[{e}*w + k]"
+            for vector in self.f.inputs
+            for e in range(self.bundle.coordinates.sizes[_SIZES[vector]])
+        } | self._prepared(self.f.shared)
+        lines = statements(self.f.unpack, self.titles, self.printer, loads)
         checks = list(self.f.unpack_checks)
         if self.first:
-            lines += statements(self.first.assignments, self.titles, self.printer)
+            lines += statements(self.first.assignments, self.titles, self.printer, loads)
             checks += self.first.checks
-        lines += [f"s->{c_name(n)}[k] = {c_name(n)};" for n in self.passed]
-        lines += self._stores(self.first)
-        lines += _flags(checks, self.printer, "t", "+=")
-        return self._routine("before", f"{self.name}_values *s", lines)
+        lines += [f"s[{at}*w + k] = {c_name(n)};" for at, n in enumerate(self.passed)]
+        lines += self._ends(self.first, checks, loads)
+        return self._routine("before", ("real *s",), lines)
 
     def after(self) -> Routine:
         """Computes what needs the sums over the legs."""
         assert self.last is not None
-        reads = symbols(self.last)
-        lines = self._passed(reads, "k")
-        lines += [
-            f"const real {c_name(n)} = s->sum[{at}][k];"
-            for at, n in enumerate(self.sums)
-            if n in reads
-        ]
-        lines += self._prepared(self.f.shared, reads)
-        lines += statements(self.last.assignments, self.titles, self.printer)
-        lines += self._stores(self.last)
-        lines += _flags(self.last.checks, self.printer, "t", "+=")
-        return self._routine("after", f"const {self.name}_values *s", lines)
+        loads = self._passed("k") | {n: f"sums[{at}*w + k]" for at, n in enumerate(self.sums)}
+        loads |= self._prepared(self.f.shared)
+        lines = statements(self.last.assignments, self.titles, self.printer, loads)
+        lines += self._ends(self.last, self.last.checks, loads)
+        return self._routine("after", ("const real *s", "const real *sums"), lines)
 
-    def _routine(self, part: str, values: str, lines: list[str]) -> Routine:
+    def _routine(self, part: str, values: tuple[str, ...], lines: list[str]) -> Routine:
         """A loop over the states around the lines."""
         parameters = [
             "const prepared *m",
             "size_t w",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
-            values,
+            *values,
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
         return Routine.of(f"{self.name}_{part}", parameters, _loop("w", lines))
 
-    def _passed(self, reads: set[str], index: str) -> list[str]:
-        return [
-            f"const real {c_name(n)} = s->{c_name(n)}[{index}];" for n in self.passed if n in reads
-        ]
+    def _passed(self, index: str) -> dict[str, str]:
+        return {n: f"s[{at}*w + {index}]" for at, n in enumerate(self.passed)}
 
-    def _prepared(self, names: Iterable[str], reads: set[str], index: str = "") -> list[str]:
-        """The prepared values that are read; names made by the function itself are its own."""
-        wanted = [n for n in names if n in reads and n not in self.made]
-        return [f"const real {c_name(n)} = m->{c_name(n)}{index};" for n in wanted]
+    def _prepared(self, names: Iterable[str], index: str = "") -> dict[str, str]:
+        """The prepared values; names made by the function itself are its own."""
+        return {n: f"m->{c_name(n)}{index}" for n in names if n not in self.made}
 
-    def _stores(self, block: Block | None) -> list[str]:
-        """Entries of the output arrays."""
+    def _ends(
+        self, block: Block | None, checks: Iterable[Check], loads: dict[str, str]
+    ) -> list[str]:
+        """Entries of the output arrays, and flags."""
         lines = []
         for store in block.stores if block else ():
             place = flat_places(store, self.columns(store.array), 1)[0]
+            lines += loaded(loads, store.value)
             lines += statement(f"{store.array}[{place}*w + k] = {self.printer.text(store.value)}")
-        return lines
+        if self.summed and block and block.stores:
+            lines += statement(f"t->total[k] += {self._summed(block)}")
+        return lines + self._flags(checks, "t->{}[k] +=", loads)
+
+    def _summed(self, block: Block) -> str:
+        """The sum of the different values that a block stores."""
+        values = [sp.sympify(s.value) for s in block.stores]
+        different = dict.fromkeys(-v if v.could_extract_minus_sign() else v for v in values)
+        return in_pairs([self.printer.text(v) for v in different if not v.is_Number] or ["0"])
 
     # ---- over the legs -----------------------------------------------------------------------
 
     def over(self, block: Block) -> Routine:
         """Computes one leg, for the legs of one state or for several states."""
-        leg, reads = block.leg_type, symbols(block)
+        leg = block.leg_type
         tables: list[str] = []
-        lines = self._passed(reads, "j")
-        lines += self._prepared(self.f.shared, reads)
-        lines += self._prepared(self.f.per_leg.get(leg, ()), reads, "[i]")
-        lines += [
-            self._leg_input(item, tables)
-            for item in self.f.leg_inputs.get(leg, ())
-            if item.symbol.name in reads
-        ]
-        lines += statements(block.assignments, self.titles, self.printer)
+        loads = self._passed("j") | self._prepared(self.f.shared)
+        loads |= self._prepared(self.f.per_leg.get(leg, ()), "[i]")
+        reads = symbols(block)
+        inputs = [i for i in self.f.leg_inputs.get(leg, ()) if i.symbol.name in reads]
+        loads |= {i.symbol.name: self._leg_input(i, leg, tables) for i in inputs}
+        lines = statements(block.assignments, self.titles, self.printer, loads)
         for n, (target, value) in enumerate(block.sums):
-            term, place = self.printer.text(value), f"o->sum[{n}][k]"
+            term, place = self.printer.text(value), f"terms[{n}*count + k]"
+            lines += loaded(loads, value)
             lines.append(f"{place} = add ? {place} + {term} : {term};  /* {target} */")
-        lines += [
-            f"o->entry[{n}][k] = {self.printer.text(store.value)};"
-            for n, store in enumerate(block.stores)
-        ]
-        lines += _flags(block.checks, self.printer, "o", "=")
+        for n, store in enumerate(block.stores):
+            lines += loaded(loads, store.value)
+            lines += statement(f"o[{n}*count + k] = {self.printer.text(store.value)}")
+        rows = {f: f"o[{n}*count + k] =" for f, n in self.flag_rows(block).items()}
+        if "total" in rows:
+            lines += statement(f"{rows['total']} {self._summed(block)}")
+        lines += self._flags(block.checks, rows, loads)
         words = words_of(lines)
-        lines = [
-            h
-            for n, h in (
-                ("i", "const size_t i = leg + legs*k;"),
-                ("j", "const size_t j = states*k;"),
-            )
-            if n in words
-        ] + lines
+        indices = {"i": "const size_t i = leg + legs*k;", "j": "const size_t j = states*k;"}
+        lines = [line for n, line in indices.items() if n in words] + lines
         parameters = [
             "const prepared *m",
             "size_t w",
             "size_t leg",
             "size_t legs",
-            f"const {self.name}_values *s",
+            "const real *s",
             "size_t states",
             "size_t count",
             "int add",
             *(f"const real *{vector_name(v)}" for v in self.f.inputs),
-            f"{self.name}_results_{leg} *o",
+            "real *terms",
+            "real *o",
         ]
         return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *_loop("count", lines)])
 
-    def _leg_input(self, item: LegInput, tables: list[str]) -> str:
-        place = _place_text(item.indices, "i", f"place_{item.symbol.name}", tables)
-        value = f"{vector_name(item.vector)}[({place})*w + j]"
-        return f"const real {c_name(item.symbol.name)} = {value};"
+    def _leg_input(self, item: LegInput, leg: str, tables: list[str]) -> str:
+        places = item.indices
+        if len(set(places)) > 1:
+            copies = capacity(self.bundle.leg_counts[leg]) - len(places)
+            places = (*places, *places[:1] * copies)
+        place = _place_text(places, "i", f"place_{item.symbol.name}", tables)
+        return f"{vector_name(item.vector)}[({place})*w + j]"
 
     def place(self, block: Block) -> Routine:
         """Puts the entries of a leg where they belong in the output arrays."""
@@ -209,15 +222,13 @@ class Parts:
         for n, store in enumerate(block.stores):
             flat = flat_places(store, self.columns(store.array), self.bundle.leg_counts[leg])
             place = _place_text(flat, "leg", f"place_{n}", tables)
-            lines.append(f"{store.array}[({place})*w + k] = o->entry[{n}][first + k];")
-        lines += [
-            f"t->{flag}[k] += o->{flag}[first + k];"
-            for flag in _TROUBLES
-            if any(c.trouble == flag for c in block.checks)
-        ]
+            lines.append(f"{store.array}[({place})*w + k] = o[{n}*count + first + k];")
+        for flag, n in self.flag_rows(block).items():
+            lines.append(f"t->{flag}[k] += o[{n}*count + first + k];")
         parameters = [
             "size_t w",
-            f"const {self.name}_results_{leg} *o",
+            "size_t count",
+            "const real *o",
             "size_t leg",
             "size_t first",
             *(f"real *{a}" for a in self.f.arrays),
@@ -225,14 +236,32 @@ class Parts:
         ]
         return Routine.of(f"{self.name}_place_{leg}", parameters, [*tables, *_loop("w", lines)])
 
-    def results(self, block: Block, width: int) -> list[str]:
-        """Fields of the structure of what the legs of a type give."""
-        fields = [f"sum[{len(block.sums)}][{width}]"] if block.sums else []
-        fields += [f"entry[{len(block.stores)}][{width}]"] if block.stores else []
-        fields += [
-            f"{flag}[{width}]" for flag in _TROUBLES if any(c.trouble == flag for c in block.checks)
-        ]
-        return fields or [f"none[{width}]"]
+    def flag_rows(self, block: Block) -> dict[str, int]:
+        """Where the flags of a leg, and the sum of its entries, stand behind these."""
+        flags = [f for f in _TROUBLES if any(c.trouble == f for c in block.checks)]
+        flags += ["total"] * bool(self.summed and block.stores)
+        return {flag: len(block.stores) + n for n, flag in enumerate(flags)}
+
+    def _flags(
+        self, checks: Iterable[Check], targets: str | dict[str, str], loads: dict[str, str]
+    ) -> list[str]:
+        """Flags of impossible states: 1 where a condition fails or is not a number."""
+        parts: dict[str, list[str]] = {}
+        lines = []
+        for check in checks:
+            lines += loaded(loads, check.value, check.scale)
+            for trouble, condition in _conditions(check, self.printer):
+                parts.setdefault(trouble, []).append(condition)
+        for trouble, conditions in parts.items():
+            text = " + ".join(f"UNLESS({c})" for c in dict.fromkeys(conditions))
+            target = targets.format(trouble) if isinstance(targets, str) else targets[trouble]
+            lines += statement(f"{target} {text}")
+        return lines
+
+
+def capacity(legs: int) -> int:
+    """Length of the model's arrays over legs: vectors of four entries, where these are worth it."""
+    return legs if legs < _WORTH else -(-legs // 4) * 4
 
 
 def _loop(count: str, lines: list[str]) -> list[str]:
@@ -252,23 +281,13 @@ def _place_text(places: tuple[int, ...], index: str, name: str, tables: list[str
     return f"{name}[{index}]"
 
 
-def _flags(checks: Iterable[Check], printer: CPrinter, target: str, operator: str) -> list[str]:
-    """Flags of impossible states: 1 where a condition fails or is not a number."""
-    parts: dict[str, list[str]] = {}
-    for check in checks:
-        value = printer.text(check.value)
-        if check.trouble == "singular":
-            tolerance = "TOLERANCE*TOLERANCE" if check.power == 2 else "TOLERANCE"
-            condition = f"magnitude({value}) > {tolerance}*{printer.text(check.scale)}"
-        elif check.trouble == "invalid":
-            # apart, as loops with conditions on conditions do not run in lanes
-            parts.setdefault("invalid", []).append(f"is_finite({value})")
-            condition = f"{value} > 0"
-        else:
-            condition = f"{value} >= 0"
-        parts.setdefault(str(check.trouble), []).append(condition)
-    lines = []
-    for trouble, conditions in parts.items():
-        text = " + ".join(f"UNLESS({c})" for c in dict.fromkeys(conditions))
-        lines += statement(f"{target}->{trouble}[k] {operator} {text}")
-    return lines
+def _conditions(check: Check, printer: CPrinter) -> list[tuple[str, str]]:
+    """What must hold, each with the trouble that it is where it does not."""
+    value, trouble = printer.text(check.value), str(check.trouble)
+    if trouble == "singular":
+        tolerance = "TOLERANCE*TOLERANCE" if check.power == 2 else "TOLERANCE"
+        return [(trouble, f"magnitude({value}) > {tolerance}*{printer.text(check.scale)}")]
+    if trouble == "invalid":
+        # apart, as loops with conditions on conditions do not run in lanes
+        return [(trouble, f"is_finite({value})"), (trouble, f"{value} > 0")]
+    return [(trouble, f"{value} >= 0")]

@@ -139,8 +139,10 @@ def _counted(bundle: Bundle, f: PublicFunction) -> str:
 class Caller:
     """Prints a function that users call: its prototypes, the call for a state and for a batch."""
 
-    def __init__(self, prefix: str, function: CFunction, steps: Routine) -> None:
-        self.prefix, self.f, self.steps = prefix, function, steps
+    def __init__(
+        self, prefix: str, function: CFunction, one: Routine, lanes: Routine | None
+    ) -> None:
+        self.prefix, self.f, self.one, self.lanes = prefix, function, one, lanes
 
     def prototypes(self) -> list[str]:
         """Comment and both prototypes."""
@@ -154,7 +156,7 @@ class Caller:
 
     def definitions(self) -> list[str]:
         """One state, and a batch."""
-        read = [parameter_name(p) for p in self.steps.parameters]
+        read = [parameter_name(p) for p in self.one.parameters]
         unread = ["model"] * (self.f.has_model and "m" not in read)
         unread += [i.name for i in self.f.inputs if i.name not in read]
         return [
@@ -162,14 +164,14 @@ class Caller:
             "{",
             "    int code;",
             *(f"    (void){name};" for name in unread),
-            *indented(self._call("1", "", "&code")),
+            *indented(self._call(self.one, "", "&code")),
             "    return code;",
             "}",
             "",
             *self._head(batch=True),
             "{",
             "    size_t failed = 0, i = 0;",
-            *(self._in_lanes() if self.f.lanes else []),
+            *(self._in_lanes(self.lanes) if self.lanes else []),
             "    for (; i < n; ++i) {",
             *indented(self._single("const int code", "i"), 2),
             "        failed += record(&code, 1, status ? status + i : NULL);",
@@ -193,7 +195,7 @@ class Caller:
         at = f"{argument.name} + {argument.size}*{count}" if count else argument.name
         return f"{argument.name} ? {at} : NULL" if argument.optional and count else at
 
-    def _call(self, w: str, count: str, code: str) -> list[str]:
+    def _call(self, steps: Routine, count: str, code: str) -> list[str]:
         """A call of the steps; NULL stands for what C has no argument for."""
         f = self.f
         given = dict.fromkeys((a.name for a in f.of.inputs), "NULL")
@@ -202,21 +204,21 @@ class Caller:
             f"{of.label}_out": self._at(o, count)
             for of, o in zip(f.of.outputs, f.outputs, strict=True)
         }
-        names = [parameter_name(p) for p in self.steps.parameters]
-        all_of = given | {"m": "model", "w": w, "code": code}
-        return listing(f"{self.steps.name}(", [all_of[n] for n in names], ");")
+        names = [parameter_name(p) for p in steps.parameters]
+        all_of = given | {"m": "model", "code": code}
+        return listing(f"{steps.name}(", [all_of[n] for n in names], ");")
 
     def _single(self, target: str, count: str) -> list[str]:
         arrays = [self._at(a, count) for a in (*self.f.inputs, *self.f.outputs)]
         head = f"{target} = {self.prefix}_{self.f.name}("
         return listing(head, ["model"] * self.f.has_model + arrays, ");")
 
-    def _in_lanes(self) -> list[str]:
+    def _in_lanes(self, steps: Routine) -> list[str]:
         """As many states as there are lanes at a time; what fails is settled one by one."""
         return [
-            "    for (; i + LANES <= n; i += LANES) {",
+            "    for (; LANES > 1 && i + LANES <= n; i += LANES) {",
             "        int codes[LANES];",
-            *indented(self._call("LANES", "i", "codes"), 2),
+            *indented(self._call(steps, "i", "codes"), 2),
             "        for (size_t k = 0; k < LANES; ++k) {",
             "            if (codes[k] != OK) {",
             *indented(self._single("codes[k]", "(i + k)"), 4),

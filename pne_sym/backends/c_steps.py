@@ -1,7 +1,8 @@
 """Public functions in C: their steps as they stand, for one state or for several side by side.
 
 An array has its states side by side: entry e of state k of w is x[e*w + k].  Operations are an
-expression of entries, a part of an operand, or a function of templates/c.
+expression of entries, a part of an operand, or a function of templates/c.  A state of its own gives
+its results where the user wants them; states side by side give theirs in the end.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_solve import Order, elimination, order_at_home
 from pne_sym.backends.c_text import WIDTH, Routine, indented, listing, statement
 from pne_sym.backends.scalar import wrap
 from pne_sym.backends.templating import render
@@ -78,6 +80,13 @@ def lanes_of(operation: str) -> bool:
     return operation in _LANES or (operation not in _SINGLE and operation != "search")
 
 
+def results_of(function: PublicFunction) -> dict[str, str]:
+    """Outputs that a function of the program gives as they are -> its name."""
+    runs = [step for step in function.steps if isinstance(step, Run)]
+    given = {t.name: run.function for run in runs for t in run.targets}
+    return {o.name: given[o.name] for o in function.outputs if o.name in given}
+
+
 def runs_in_lanes(function: PublicFunction) -> bool:
     """Whether a batch runs several states side by side: one run of the legs, and what can be."""
     runs = [step for step in function.steps if isinstance(step, Run)]
@@ -102,7 +111,8 @@ class Steps:
         function: what is printed.
         runs: routines that run the functions of the program, by name.
         parts: routines of the functions that it searches with, by name.
-        lanes: for states side by side; by default where these are used.
+        eliminations: routines that solve small systems, by order; new ones are added.
+        lanes: for states side by side.
     """
 
     def __init__(
@@ -111,12 +121,14 @@ class Steps:
         function: PublicFunction,
         runs: Mapping[str, Routine],
         parts: Mapping[str, Routine],
+        eliminations: dict[Order, Routine],
         *,
-        lanes: bool | None = None,
+        lanes: bool,
     ) -> None:
         self.bundle, self.f, self.runs, self.parts = bundle, function, runs, parts
-        self.lanes = runs_in_lanes(function) if lanes is None else lanes
-        self.w = "w" if self.lanes else "1"
+        self.eliminations = eliminations
+        self.lanes = lanes
+        self.w = "LANES" if self.lanes else "1"
         self.read = interpret.inputs_read(bundle.program, function)
         applied = [step for step in function.steps if isinstance(step, Apply)]
         self.used = {o.name for step in applied for o in step.operands}
@@ -124,6 +136,7 @@ class Steps:
         self.at = {a.name: a.name for a in function.inputs}
         self.buffers: list[str] = []
         self.tables: list[str] = []
+        self.summed = set[str]()
         self.work = 0
         self.before: list[str] = []
 
@@ -132,19 +145,12 @@ class Steps:
         lines = [f"start({self.w}, &why);", *self._inputs()]
         for step in self.f.steps:
             lines += self._step(step)
-        outputs = [o for o in self.f.outputs if o.value.size]
-        for o in outputs:
-            lines.append(f"check({o.value.size}, {self.w}, {self.at[o.name]}, why.overflow);")
-        lines.append(f"judge(&why, {self.w}, code);")
-        for o in outputs:
-            at = f"{self.at[o.name]}, {o.value.size}, {self.w}, code"
-            lines.append(f"deliver({at}, {o.label}_out);")
+        lines += self._outputs()
         if self.work:
             self.buffers.append(self._buffer("work", self.work))
         head = [*self.tables, *(listing("real ", self.buffers, ";") if self.buffers else [])]
         parameters = [
             "const prepared *m",
-            "size_t w",
             *(f"const real *{name}" for name in c_order([a.name for a in self.f.inputs])),
             *(f"real *{o.label}_out" for o in self.f.outputs),
             "int *code",
@@ -153,44 +159,89 @@ class Steps:
         # once in the function that users call; apart where several call it
         alone = self.f.is_exported and "weights" not in self.read
         kind = "INLINE" if alone else "static"
-        return Routine.of(f"{self.f.name}_any", parameters, body, kind)
+        name = f"{self.f.name}_{'lanes' if self.lanes else 'one'}"
+        return Routine.of(name, parameters, body, kind)
+
+    def _outputs(self) -> list[str]:
+        """The verdict, and results where the user wants them."""
+        outputs = [o for o in self.f.outputs if o.value.size]
+        wanted = {o.name: f"{o.label}_out" for o in outputs}
+        apart = [o for o in outputs if o.name not in self.summed]
+        moved = [o for o in outputs if self.at[o.name] != wanted[o.name]]
+        move = "deliver" if self.lanes else "copy"
+        moves = [f"{move}({o.value.size}, {self.at[o.name]}, {wanted[o.name]});" for o in moved]
+        if self.lanes:
+            sums = [f"add_up({o.value.size}, {self.at[o.name]}, why.total);" for o in apart]
+            return [*sums, "suspect(&why, code);", *moves]
+        checks = {
+            o.name: f"check({o.value.size}, 1, {self.at[o.name]}, why.overflow);" for o in outputs
+        }
+        summed = [checks.pop(name) for name in [*checks] if name in self.summed]
+        lines = [*checks.values(), "judge(&why, code);", *moves]
+        if summed:
+            lines[:0] = ["if (!is_finite(why.total[0])) {", *indented(summed), "}"]
+        refused = [f"refuse({o.value.size}, {wanted[o.name]});" for o in outputs]
+        return [*lines, "if (*code != OK) {", *indented(refused), "}"]
 
     # ---- arrays ------------------------------------------------------------------------------
 
     def _by(self, size: int) -> str:
         """So many entries of every state."""
-        return f"{size}*w" if self.lanes else str(size)
+        return f"{size}*LANES" if self.lanes else str(size)
 
     def _buffer(self, name: str, size: int) -> str:
         return f"{name}[{size}*LANES]" if self.lanes else f"{name}[{size}]"
 
-    def _made(self, value: Value, *, zero: bool = False) -> str:
+    def _given(self, step: Step, value: Value) -> str:
+        """Where the user wants a value that can be written there at once; "" for none.
+
+        What the user gives may be overwritten only when nothing reads it any more.
+        """
+        names = {a.name for a in self.f.inputs}
+        wanted = [o.label for o in self.f.outputs if o.name == value.name]
+        later = self.f.steps[self.f.steps.index(step) :]
+        readers = [s for s in later if _reads(s, names)]
+        if isinstance(step, Run) and not self.bundle.program.functions[step.function].leg_inputs:
+            readers.remove(step)
+        written = isinstance(step, Run) or (isinstance(step, Apply) and step.operation == "solve")
+        return f"{wanted[0]}_out" if wanted and written and not (self.lanes or readers) else ""
+
+    def _made(self, value: Value, step: Step | None = None, *, zero: bool = False) -> str:
         """An array for a value; zero where analysers do not see that all of it is written."""
         self.at[value.name] = value.name if value.size else "NULL"
-        if value.size:
+        given = self._given(step, value) if step else ""
+        if given:
+            self.at[value.name] = given
+        elif value.size:
             zeroed = " = {0}" * (zero or not self.lanes)
             self.buffers.append(self._buffer(value.name, value.size) + zeroed)
         return self.at[value.name]
 
     def _inputs(self) -> list[str]:
         """Inputs that are read, their states side by side; q0 is taken where loops are closed."""
-        lines = []
+        lines, checks = [], {}
         for a in self.f.inputs:
             if a.name not in self.read or a.default is Default.HOME_Q or not a.value.size:
                 continue
-            given = f"{a.value.size}, {self.w}, {a.name}"
+            given, own = f"{a.value.size}, {a.name}", f"{a.name}_in"
             if a.positive:
-                lines.append(f"require_positive({given}, why.invalid);")
+                lines.append(f"require_positive({a.value.size}, {self.w}, {a.name}, why.invalid);")
             if a.default or self.lanes:
-                self.buffers.append(self._buffer(f"{a.name}_in", a.value.size))
+                self.buffers.append(self._buffer(own, a.value.size))
+            ends = f"{own}, why.{'total' if self.lanes else 'invalid'}"
             if a.default:
-                fill = _FILL[a.default]
-                lines.append(f"{a.name} = optional({given}, {fill}, {a.name}_in, why.invalid);")
+                call = "optional_side_by_side" if self.lanes else "optional"
+                lines.append(f"{a.name} = {call}({given}, {_FILL[a.default]}, {ends});")
             elif self.lanes:
-                lines.append(f"{a.name} = side_by_side({given}, {a.name}_in, why.invalid);")
+                lines.append(f"{a.name} = side_by_side({given}, {ends});")
             else:
-                lines.append(f"check({given}, why.invalid);")
-        return lines
+                check = f"check({a.value.size}, 1, {a.name}, why.invalid);"
+                checks[f"total({a.name}, {a.value.size})"] = check
+        if len(checks) > 1:
+            head = statement(f"const real total_in = {' + '.join(checks)}")
+            body = indented(checks.values())
+            return [*head, "if (!is_finite(total_in)) {", *body, "}", *lines]
+        return [*checks.values(), *lines]
 
     # ---- steps -------------------------------------------------------------------------------
 
@@ -206,8 +257,11 @@ class Steps:
         if "q" in function.inputs and "joints" not in self.at:
             joints = Value("joints", (self.bundle.coordinates.sizes["NJ"],))
             lines.append(f"close_loops(m, {self.w}, X, q0, {self._made(joints)}, &why);")
-        arrays = {a: self._made(t) for a, t in zip(function.arrays, step.targets, strict=True)}
-        call = self.runs[step.function].call_with({"w": self.w, "t": "&why", **arrays})
+        targets = zip(function.arrays, step.targets, strict=True)
+        arrays = {a: self._made(t, step) for a, t in targets}
+        if set(results_of(self.f)) & {t.name for t in step.targets}:
+            self.summed |= {t.name for t in step.targets}
+        call = self.runs[step.function].call_with({"t": "&why", **arrays})
         return [*lines, *wrap(call, WIDTH - 4, "    ")]
 
     def _part(self, step: Apply) -> list[str]:
@@ -240,13 +294,13 @@ class Steps:
         if in_place:
             self.at[step.targets[0].name] = "work"
         zero = name not in _ENTRIES and name != "solve"
-        targets = ["work"] if in_place else [self._made(t, zero=zero) for t in step.targets]
+        targets = ["work"] if in_place else [self._made(t, step, zero=zero) for t in step.targets]
         if not any(t.size for t in step.targets):
             return []
         fields = self._fields(step, targets)
         lines = []
-        if name == "solve" and fields["a"] != "work":
-            lines.append("set_matrix({m}, {w}, {a}, work);".format(**fields))
+        if name == "solve":
+            return self._solve(step, fields)
         if name in _ENTRIES:
             entry = _ENTRIES[name].format(**fields) if step.operands[0].size else "0"
             body = indented(statement(f"{targets[0]}[i] = {entry}"))
@@ -260,6 +314,54 @@ class Steps:
             self.tables.append(f"static const size_t {table}[] = {{{rows}}};")
             fields["places"] = table
         return [*lines, *(wrap(call.format(**fields), WIDTH - 4, "    ") if call else [])]
+
+    def _solve(self, step: Apply, fields: dict[str, object]) -> list[str]:
+        """Linear equations: straight through in the order of home, or with a choice of pivots.
+
+        States side by side that are in doubt are left to be solved one by one.
+        """
+        filled = fields["a"] == "work"
+        careful = [] if filled else ["set_matrix({m}, {w}, {a}, work);".format(**fields)]
+        order = order_at_home(self.bundle, self.f, step)
+        if self.lanes:
+            careful.append(_LANES["solve"].format(**fields))
+        else:
+            call = (
+                _SINGLE["solve"]
+                if order is None
+                else "solve_apart({m}, {b}, work, {x}, why.singular);"
+            )
+            careful.append(call.format(**fields))
+        if order is None:
+            self._needs_work(step)
+            return careful
+        if order not in self.eliminations:
+            self.eliminations[order] = elimination(f"eliminate_{len(self.eliminations)}", order)
+            self.before.append("\n".join(self.eliminations[order].definition()))
+        names = {v: str(fields[v]) for v in "abx"}
+        stride = f"stride_of({fields['m']}, {self.w})" if filled else str(fields["m"])
+        names |= {"w": self.w, "stride": stride, "unsure": "why.singular", "total": "why.total"}
+        self.summed.add(step.targets[0].name)
+        straight = self.eliminations[order]
+        if self.lanes:
+            if filled:
+                self._needs_work(step)
+            return [straight.call_with(names)]
+        self._needs_work(step)
+        unsure = f"unsure_{len(self.buffers)}"
+        self.buffers.append(f"{unsure}[1] = {{0}}")
+        careful.append("check({m}, 1, {x}, why.overflow);".format(**fields))
+        return [
+            straight.call_with(names | {"unsure": unsure}),
+            f"if ({unsure}[0] > 0) {{",
+            *indented(careful),
+            "}",
+        ]
+
+    def _needs_work(self, step: Apply) -> None:
+        """Room for a system."""
+        m = step.operands[0].shape[0]
+        self.work = max(self.work, m * padded(m))
 
     def _is_solved(self, step: Apply) -> bool:
         """Whether the result is a matrix that stands where the next solution finds it."""
@@ -277,8 +379,6 @@ class Steps:
         m, n = (*step.operands[0].shape, 1, 1)[:2]
         p = (*step.operands[1].shape, 1, 1)[1] if len(step.operands) > 1 else 1
         size = step.targets[0].size
-        if step.operation == "solve":
-            self.work = max(self.work, m * padded(m))
         stride = f"stride_of({m + p}, {self.w})" if "work" in targets else m + p
         return {
             **dict(zip("abc", (self.at[o.name] for o in step.operands), strict=False)),
@@ -316,6 +416,11 @@ class Steps:
         self.before.append(text)
         arguments = ", ".join(("m", *others, step.start.name, self._made(step.target)))
         return [f"blame(search_{step.residual}({arguments}), &why);"]
+
+
+def _reads(step: Step, names: set[str]) -> bool:
+    """Whether a step reads any of these arrays; a function, or a search, reads the inputs."""
+    return not isinstance(step, Apply) or any(o.name in names for o in step.operands)
 
 
 def padded(n: int) -> int:

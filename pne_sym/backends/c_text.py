@@ -93,6 +93,19 @@ def listing(head: str, items: Sequence[str], tail: str, indent: str = "    ") ->
     return wrap(f"{head}{', '.join(items)}{tail}", WIDTH, indent)
 
 
+def in_pairs(terms: Sequence[str]) -> str:
+    """A sum in pairs: shorter to wait for than one after another.
+
+    >>> in_pairs(["a", "b", "c", "d", "e"])
+    '(a + b) + (c + (d + e))'
+    """
+    half = len(terms) // 2
+    if not half:
+        return terms[0]
+    parts = (in_pairs(part) for part in (terms[:half], terms[half:]))
+    return " + ".join(f"({p})" if " + " in p else p for p in parts)
+
+
 def table(places: Sequence[int], index: str) -> str | None:
     """Index of the place of a leg, where the places are evenly spaced; None where not.
 

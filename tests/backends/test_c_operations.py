@@ -43,11 +43,9 @@ def function(operation: str, shapes: tuple[Shape, ...], numbers: tuple[int, ...]
 
 def exported(number: int, routine: Routine, *, lanes: bool) -> list[str]:
     """A function that calls the routine."""
-    declared = [p for p in routine.parameters if parameter_name(p) != "w"]
-    names = ["LANES"] * lanes + [parameter_name(p) for p in declared]
-    call = f"{routine.name}({', '.join(names)});"
-    head = f"void run_{number}{'_lanes' if lanes else ''}({', '.join(declared)})"
-    return [*routine.definition(), f"{head};", f"{head} {{ {call} }}"]
+    names = ", ".join(parameter_name(p) for p in routine.parameters)
+    head = f"void run_{number}{'_lanes' if lanes else ''}({', '.join(routine.parameters)})"
+    return [*routine.definition(), f"{head};", f"{head} {{ {routine.name}({names}); }}"]
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +55,7 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     lines = []
     for number, case in enumerate(LISTED):
         for lanes in [False, True] if lanes_of(case[0]) else [False]:
-            routine = Steps(bundle, function(*case), {}, {}, lanes=lanes).routine()
+            routine = Steps(bundle, function(*case), {}, {}, {}, lanes=lanes).routine()
             name = f"of_{number}{'_lanes' if lanes else ''}"
             routine = Routine(name, routine.parameters, routine.body, routine.kind)
             lines += exported(number, routine, lanes=lanes)
@@ -99,15 +97,21 @@ def test_they_are_what_is_defined(library: ctypes.CDLL, number: int) -> None:
     made = OPERATIONS[operation].shapes(shapes, numbers)
     one = getattr(library, f"run_{number}")
     single = [called(one, [a[k : k + 1] for a in given], made, 1) for k in range(LANES)]
-    answers = [([np.concatenate(o) for o in zip(*(o for o, _ in single), strict=True)],
-                np.concatenate([c for _, c in single]))]  # fmt: skip
+    outputs = [np.concatenate(o) for o in zip(*(o for o, _ in single), strict=True)]
+    np.testing.assert_array_equal(np.concatenate([c for _, c in single]), codes)
+    assert_right(outputs, wanted, good, operation)
+    assert all(np.isnan(a[~good]).all() for a in outputs)
     if lanes_of(operation):
-        answers.append(called(getattr(library, f"run_{number}_lanes"), given, made, LANES))
-    for outputs, found in answers:
-        np.testing.assert_array_equal(found, codes)
-        for a, b in zip(outputs, wanted, strict=True):
-            rows = [np.swapaxes(v, -1, -2) if operation == "resolve" else v for v in (a, b)]
-            if operation in PROJECTED:
-                rows = [v @ np.swapaxes(v, -1, -2) for v in rows]
-            np.testing.assert_allclose(rows[0][good], rows[1][good], rtol=1e-11, atol=1e-12)
-            assert np.isnan(a[~good]).all()
+        outputs, found = called(getattr(library, f"run_{number}_lanes"), given, made, LANES)
+        assert (codes[found == 0] == 0).all()  # others are settled one by one
+        assert (found[codes == 0] == 0).all()
+        assert_right(outputs, wanted, good, operation)
+
+
+def assert_right(outputs: list[Any], wanted: Any, good: Any, operation: str) -> None:
+    """Outputs are what is wanted where the state is good."""
+    for a, b in zip(outputs, wanted, strict=True):
+        rows = [np.swapaxes(v, -1, -2) if operation == "resolve" else v for v in (a, b)]
+        if operation in PROJECTED:
+            rows = [v @ np.swapaxes(v, -1, -2) for v in rows]
+        np.testing.assert_allclose(rows[0][good], rows[1][good], rtol=1e-11, atol=1e-12)

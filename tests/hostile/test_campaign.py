@@ -79,8 +79,8 @@ def test_hostile_states_break_no_promise(which: str, build: str, tmp_path: Path)
 
 
 DELIVER = """for (size_t e = 0; e < size; ++e) {
-        for (size_t k = 0; k < w; ++k) {
-            out[size*k + e] = x[e*w + k];
+        for (size_t k = 0; k < LANES; ++k) {
+            out[size*k + e] = x[e*LANES + k];
 """
 VERDICT = "    verdict why;\n"
 PLANTED = {
@@ -89,7 +89,7 @@ PLANTED = {
     "a word too many": (
         "quick",
         DELIVER,
-        f"{DELIVER}            out[size*w] = 0;\n",
+        f"{DELIVER}            out[size*LANES] = 0;\n",
         "writes beyond its output",
     ),
     "failures are not counted": (
