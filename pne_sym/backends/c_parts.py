@@ -40,14 +40,24 @@ def statements(
     assignments: Iterable[Assignment], titles: dict[str, str], printer: CPrinter
 ) -> list[str]:
     """Assignments, headed by the equations they belong to."""
+    return headed(
+        (
+            (a.equation, statement(f"const real {c_name(str(a.target))} = {printer.text(a.expr)}"))
+            for a in assignments
+        ),
+        titles,
+    )
+
+
+def headed(rows: Iterable[tuple[str, list[str]]], titles: dict[str, str]) -> list[str]:
+    """Lines with the equations they belong to, under these."""
     lines: list[str] = []
-    equation = ""
-    for a in assignments:
-        if a.equation != equation:
-            equation = a.equation
-            title = titles.get(equation, "")
+    known = ""
+    for equation, own in rows:
+        if equation != known:
+            known, title = equation, titles.get(equation, "")
             lines += comment(f"({equation}) {title}" if title else f"{equation}: named entries")
-        lines += statement(f"const real {c_name(str(a.target))} = {printer.text(a.expr)}")
+        lines += own
     return lines
 
 
@@ -145,11 +155,12 @@ class Parts:
 
     def _stores(self, block: Block | None) -> list[str]:
         """Entries of the output arrays."""
-        lines = []
+        rows = []
         for store in block.stores if block else ():
             place = flat_places(store, self.columns(store.array), 1)[0]
-            lines += statement(f"{store.array}[{place}*w + k] = {self.printer.text(store.value)}")
-        return lines
+            value = self.printer.text(store.value)
+            rows.append((store.equation, statement(f"{store.array}[{place}*w + k] = {value}")))
+        return headed(rows, self.titles)
 
     # ---- over the legs -----------------------------------------------------------------------
 
@@ -166,13 +177,15 @@ class Parts:
             if item.symbol.name in reads
         ]
         lines += statements(block.assignments, self.titles, self.printer)
+        rows = []
         for n, (target, value) in enumerate(block.sums):
             term, place = self.printer.text(value), f"o->sum[{n}][k]"
-            lines.append(f"{place} = add ? {place} + {term} : {term};  /* {target} */")
-        lines += [
-            f"o->entry[{n}][k] = {self.printer.text(store.value)};"
-            for n, store in enumerate(block.stores)
-        ]
+            text = f"{place} = add ? {place} + {term} : {term};  /* {target} */"
+            rows.append((block.sum_equations[n], [text]))
+        for n, store in enumerate(block.stores):
+            text = f"o->entry[{n}][k] = {self.printer.text(store.value)};"
+            rows.append((store.equation, [text]))
+        lines += headed(rows, self.titles)
         lines += _flags(block.checks, self.printer, "o", "=")
         words = words_of(lines)
         lines = [

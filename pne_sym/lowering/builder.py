@@ -7,8 +7,8 @@ parameters alone is told apart by its stage.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -47,6 +47,13 @@ class Guard:
     power: int
     stage: Stage
     equation: str
+
+    def rewritten(self, changes: Mapping[Any, Any]) -> Guard:
+        """With other expressions for its values; of a tested pivot the sign says nothing."""
+        value, scale = (sp.sympify(e).xreplace(changes) for e in (self.value, self.scale))
+        if self.trouble == "singular":
+            value = algebra.signed(value)[1]
+        return replace(self, value=value, scale=scale)
 
 
 @dataclass(frozen=True)
@@ -374,6 +381,17 @@ class Builder:
         for hint, before, after in forgotten.issues:
             self._issues.append((hint, before))
             self._issued[hint] = after
+
+    def rewrite(self, expressions: Mapping[Any, Any], changes: Mapping[Any, Any]) -> None:
+        """Other expressions for the same values, or for their negatives.
+
+        Args:
+            expressions: of every statement's target.
+            changes: what stands for the values in guards; of tested pivots the sign says nothing.
+        """
+        self.statements = [replace(s, expr=expressions[s.target]) for s in self.statements]
+        self.of = {s.target: s for s in self.statements}
+        self.guards = [guard.rewritten(changes) for guard in self.guards]
 
     def cost(self, atoms: Iterable[Atom]) -> int:
         """Run-time operations needed for the atoms beyond what is live already."""

@@ -15,6 +15,8 @@ import pytest
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.emission import emit
 from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.margins import OWN_NAMES
+from pne_sym.lowering.meaning import Meaning
 from pne_sym.lowering.program import lower
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.count import count_function
@@ -64,9 +66,12 @@ def test_a_common_prefix_is_all_that_changes(name: str, monkeypatch: pytest.Monk
 
     def recorded(self: Builder, expr: Any, stage: Any, hint: str, *more: Any, **others: Any) -> Any:
         hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
-        return record(self, expr, stage, prefixed(hint), *more, **others)
+        hint = hint if hint in OWN_NAMES else prefixed(hint)
+        return record(self, expr, stage, hint, *more, **others)
 
     monkeypatch.setattr(Builder, "_record", recorded)
+    stem = Meaning.stem
+    monkeypatch.setattr(Meaning, "stem", lambda *given: prefixed(stem(*given)))
     after = emit(under_other_names(manipulator, prefixed), TARGETS)
     assert before.keys() == after.keys()
     for file, text in before.items():
